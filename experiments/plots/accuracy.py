@@ -90,14 +90,14 @@ def accuracy_curves(results, _):
     cost, fetches = ("cost_ms_median", "trace + structures, ms"), ("fetches_mean", "fetches per ray")
     note = "lines: Pareto fronts; bars: 95 % CI, hollow: not known; dotted: no error"
     for title, name, rows in results.pictures():
-        if len(rows) < 5 or not results.swept(rows):
+        if len(rows) < FEWEST_RUNS or not results.swept(rows):
             continue
         for prefix, truth in TRUTHS:
             recall, precision, f1 = (f"{prefix}{one}_1px" for one in ("recall", "precision", "f1"))
             for file, message, panels in (
                     (recall, (recall, "recall"), ((recall, "recall", *cost), (recall, "recall", *fetches))),
                     (f"{prefix}precision_f1", (f1, "F1"), ((precision, "precision", *cost), (f1, "F1", *cost)))):
-                if any(column not in rows or rows[column].notna().sum() < 5 for column, *_ in panels):
+                if any(column not in rows or rows[column].notna().sum() < FEWEST_RUNS for column, *_ in panels):
                     continue
                 height = height_beside(short_names(lines_of(rows).unique()).values(), 1.9)
                 figure, axes = sheet(height, height)

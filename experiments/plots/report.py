@@ -143,7 +143,7 @@ def ranking_text(results, chosen):
             "one that never does, at its nearest setting, behind the others. ")
     if chosen.worse_surface.any():
         text += ("A worse surface model makes a tracer cheaper and its answers worse. So those over a surface model stand behind the others "
-                 "where the same technique has a better F1 over another model. ")
+                 "where the same technique has an F1 more than a point better over another model. ")
     return text + (f"Shares are means over {frames} frames, times and the ends of their intervals geometric means." if frames > 1 else "")
 
 

@@ -165,6 +165,8 @@ def lost_by_class(results, tables):
         return
     names = frame_labels(rows)
     first = rows[rows.place == 0].drop_duplicates("frame_name").iloc[::-1]
+    if not sum(first[f"handed_{cls}"].sum() for cls in LOST):
+        return
     figure, ((axis,),) = sheet(0.75 + 0.17 * len(first))
     left = np.zeros(len(first))
     for cls, word in LOST.items():

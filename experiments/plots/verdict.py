@@ -6,7 +6,7 @@ from .accuracy import ratio_of_rows
 from .data import describe
 
 F1_SLACK = 0.01
-MISSES = {"visible_displaced": "hit another point", "missed_not_in_depth": "are not in the depth buffer", "missed_stopped": "are stopped",
+MISSES = {"visible_displaced": "hit another point", "missed_not_in_depth": "are missed by exact tracers as well", "missed_stopped": "are stopped",
           "missed_stepped_over": "are stepped over", "missed_out_of_steps": "run out of steps",
           "missed_facing_rule": "are refused by the facing rule"}
 FALSE_HITS = {"false_self": "on the reflector itself", "false_too_thick": "behind a surface that is taken too thick",
@@ -123,21 +123,22 @@ def named(row):
     return f"{name} ({setting})" if comma else name
 
 
-def causes(row, names, floor=0.0005):
-    """The two largest, "7.1 % are not in the depth buffer, 2 % hit another point"."""
-    shares = sorted(((row[name], said) for name, said in names.items() if has_value(row, name) and row[name] >= floor), reverse=True)
-    return ", ".join(f"{percent(share)} {said}" for share, said in shares[:2])
+def causes(row, total, names, floor=0.0005):
+    """The two largest, and the rest of the total: ": 7 % are stopped, 2 % hit another point, 1 % for other reasons"."""
+    shares = sorted(((row[name], said) for name, said in names.items() if has_value(row, name) and row[name] >= floor), reverse=True)[:2]
+    said = [f"{percent(share)} {cause}" for share, cause in shares]
+    rest = total - sum(share for share, _ in shares)
+    return ": " + ", ".join(said + [f"{percent(rest)} for other reasons"] * (rest >= floor)) if said else ""
 
 
 def left_wrong(row):
     """What the chosen tracer still gets wrong, and why: sentences."""
     sentences = []
     if has_value(row, "recall_1px"):
-        missed = causes(row, MISSES)
-        sentences.append(f"It misses {percent(1 - row.recall_1px)} of what the frame shows" + (f": {missed}." if missed else "."))
+        missed = 1 - row.recall_1px
+        sentences.append(f"It misses {percent(missed)} of what the frame shows{causes(row, missed, MISSES)}.")
     if has_value(row, "false_hits"):
-        wrong = causes(row, FALSE_HITS)
-        sentences.append(f"{percent(row.false_hits)} of its rays end in a false hit" + (f": {wrong}." if wrong else "."))
+        sentences.append(f"{percent(row.false_hits)} of its rays end in a false hit{causes(row, row.false_hits, FALSE_HITS)}.")
     return " ".join(sentences)
 
 

@@ -36,6 +36,8 @@ std::string no_hits_text(const Technique& technique, const TraceSettings& settin
     std::string  text = fmt::format("warning: {}: {} of {} rays hit. It sees the depth buffer only at its samples. ",
                                     technique.id, counts.hits, counts.rays);
     if (settings.thickness_m <= 0) return text + "A sample needs a thickness to hit: -p thickness_m=0.1";
+    if (extent_m > 0 && settings.max_distance_m <= extent_m)
+        return text + "They may lie too far apart: take more steps, or a larger thickness_m";
     text += fmt::format("With max_distance_m = {} they may lie too far apart", settings.max_distance_m);
     return text + (extent_m > 0 ? fmt::format(": -p max_distance_m={} is about the scene's size", extent_m) : "");
 }

@@ -122,8 +122,8 @@ class Test(Case):
         (_, text), = plots.verdict.verdicts(results, chosen)
         self.assertEqual(text, "linear (steps 40) is one of the cheapest tracers that find 99 % of what the depth buffer holds: 2 ms, "
                                "as fast as dda within the noise: 1.05 [0.9, 1.3] times. In brackets: 95 % intervals. "
-                               "It misses 10 % of what the frame shows: 7 % are not in the depth buffer, 2 % hit another point. "
-                               "5 % of its rays end in a false hit: 3 % behind a surface that is taken too thick, 1.5 % on the reflector itself.")
+                               "It misses 10 % of what the frame shows: 7 % are missed by exact tracers as well, 2 % hit another point, 1 % for other reasons. "
+                               "5 % of its rays end in a false hit: 3 % behind a surface that is taken too thick, 1.5 % on the reflector itself, 0.5 % for other reasons.")
         (_, text), = plots.verdict.verdicts(results, chosen[~chosen.reached])
         self.assertEqual(text, "No tracer finds 99 % of what the depth buffer holds. The nearest is march (steps 40): 80 % in 3 ms.")
         results.targets = {"recall_1px": [0.5, 0.995]}
