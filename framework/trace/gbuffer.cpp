@@ -54,7 +54,8 @@ TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px)
         return make_texel_buffer(gpu, static_cast<uint64_t>(tiles.x) * tiles.y * sizeof(glm::uvec2),
                                        vk::Format::eR32Uint);
     };
-    return {two_words(), make_buffer(gpu, 16), two_words(), make_buffer(gpu, 16),
+    const glm::uvec4 none(0);
+    return {two_words(), make_buffer_with<glm::uvec4>(gpu, std::span(&none, 1)), two_words(), make_buffer(gpu, 16),
             make_buffer(gpu, sizeof(GBufferCounts))};
 }
 

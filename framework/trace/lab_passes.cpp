@@ -149,19 +149,6 @@ ShaderSource ray_setup_source(const Gpu& gpu, const RayBuffers& rays)
     return {.file = "rays/rays.comp", .defines = defines};
 }
 
-namespace {
-
-/// One workgroup lists the tiles: as wide as every device allows, and as wide as this one allows where passes are parallel.
-Shader compile_tile_list(const Gpu& gpu)
-{
-    const uint32_t most        = std::min(gpu.impl->limits.maxComputeWorkGroupInvocations, 1024U);
-    const uint32_t invocations = gpu.info.lanes > 1 ? std::bit_floor(most) : 128;
-    return compile_shader(
-        gpu, {.file = "rays/tile_list.comp", .defines = {{"TILE_LIST_INVOCATIONS", std::to_string(invocations)}}});
-}
-
-} // namespace
-
 Constants trace_constants(const Gpu& gpu, const Lab& lab, const RayBuffers& rays)
 {
     const std::string exact = exact_choice(lab.technique, lab.values);
@@ -196,12 +183,17 @@ void record_technique(const Commands& commands, const TechniquePasses& passes, c
 
 namespace {
 
+/// As many invocations a workgroup as all devices allow, or as this one allows where passes are parallel: the last one
+/// lists all tiles.
 Classification make_classification(Gpu& gpu, const Bindings& bindings, const Constants& constants)
 {
-    const bool  by_pixel = gpu.info.lanes > 1;
-    const char* file     = by_pixel ? "rays/classification_by_pixel.comp" : "rays/classification.comp";
-    return {.pass            = make_compute_pass(gpu, compile_shader(gpu, {.file = file}), bindings, constants),
-            .tiles_per_group = by_pixel ? uint32_t{CLASSIFIED_TILES_BY_PIXEL} : uint32_t{CLASSIFIED_TILES}};
+    const bool     by_pixel = gpu.info.lanes > 1;
+    const uint32_t most = std::min(gpu.impl->limits.maxComputeWorkGroupInvocations, 64U * CLASSIFIED_TILES_BY_PIXEL);
+    const uint32_t invocations = by_pixel ? std::bit_floor(most) : uint32_t{CLASSIFIED_TILES};
+    const char*    file        = by_pixel ? "rays/classification_by_pixel.comp" : "rays/classification.comp";
+    const Shader   shader =
+        compile_shader(gpu, {.file = file, .defines = {{"CLASSIFICATION_INVOCATIONS", std::to_string(invocations)}}});
+    return {make_compute_pass(gpu, shader, bindings, constants), by_pixel ? invocations / 64 : invocations};
 }
 
 } // namespace
@@ -222,7 +214,6 @@ TracePasses make_trace_passes(Gpu& gpu, const Lab& lab, const RayBuffers& rays, 
     constants.add(CONSTANT_RAYS_PER_WORKGROUP, rays_per_workgroup(gpu));
     TracePasses passes;
     passes.classification = make_classification(gpu, bindings, constants);
-    passes.tile_list      = make_compute_pass(gpu, compile_tile_list(gpu), bindings, constants, sizeof(glm::ivec2));
     passes.rays      = make_compute_pass(gpu, compile_shader(gpu, ray_setup_source(gpu, rays)), bindings, constants);
     passes.technique = make_technique_passes(gpu, lab, rays, bindings);
     return passes;
@@ -244,9 +235,6 @@ void record_classification(const Commands& commands, const TracePasses& passes, 
 {
     barrier(commands);
     record_marking(commands, passes.classification, gbuffer);
-    push(commands, passes.tile_list, glm::ivec2(groups_of_8(gbuffer.view.size_px)));
-    dispatch(commands, passes.tile_list, {1, 1, 1});
-    barrier(commands);
 }
 
 void record_ray_setup(const Commands& commands, const TracePasses& passes, const GBuffer& gbuffer)
@@ -270,6 +258,8 @@ const GBufferCounts& count_gbuffer(Gpu& gpu, GBuffer& gbuffer, const TraceSettin
     bindings.insert({{"View", gbuffer.view_uniforms},
                      {"TileMasks", gbuffer.tiles.masks},
                      {"PictureStatistics", gbuffer.tiles.statistics}});
+    for (const char* unused : {"TileLaunch", "TileCount", "Tiles", "RayCount", "RayLaunch", "GroupLaunch"})
+        bindings.insert({unused, gbuffer.tiles.launch}); // no list is made
     Constants constants;
     add_reflecting(constants, settings);
     constants.add(CONSTANT_COUNTS_PIXELS, 1);

@@ -65,7 +65,7 @@ struct TechniquePasses {
     ComputePass                  trace;
 };
 
-/// The pass that marks tiles, with the number of adjacent tiles per workgroup.
+/// The pass that marks and lists tiles, with the number of adjacent tiles per workgroup.
 struct Classification {
     ComputePass pass;
     uint32_t    tiles_per_group = 1;
@@ -73,7 +73,7 @@ struct Classification {
 
 struct TracePasses {
     Classification  classification;
-    ComputePass     tile_list, rays;
+    ComputePass     rays;
     TechniquePasses technique;
 };
 

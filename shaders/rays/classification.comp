@@ -5,13 +5,10 @@
 #error four bins in each of four words
 #endif
 
-layout(local_size_x = CLASSIFIED_TILES) in;
+layout(local_size_x = CLASSIFICATION_INVOCATIONS) in;
 
-void main()
+void mark(ivec2 tile)
 {
-    ivec2 tiles = (size_px + 7) / 8, tile = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(tile, tiles))) return;
-
     const int per_block = block_px * block_px, blocks_x = 8 / block_px;
     uvec2     mask = uvec2(0), first = uvec2(0); // of the tile; of the pixel from which the block is traced
     int       first_rank = 1 << 16;
@@ -44,7 +41,7 @@ void main()
         first      = last ? uvec2(0) : first;
         first_rank = last ? 1 << 16 : first_rank;
     }
-    tile_masks[tile.y * tiles.x + tile.x] = mask;
+    tile_masks[tile.y * size_tiles.x + tile.x] = mask;
     if (surfaces > 0) atomicAdd(surface_pixels, surfaces);
     if (mirrors == 0) return;
     atomicAdd(reflecting_pixels, mirrors);
@@ -54,4 +51,11 @@ void main()
         uint count = roughness[bin >> 2] >> 8 * (bin & 3) & 0xFFu;
         if (count > 0) atomicAdd(roughness_pixels[bin], count);
     }
+}
+
+void main()
+{
+    ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
+    if (all(lessThan(tile, size_tiles))) mark(tile);
+    if (counts_pixels == 0) list_tiles();
 }

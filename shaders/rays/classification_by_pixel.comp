@@ -3,11 +3,11 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 
-const int tiles_at_once = 2;
+const int group_tiles = CLASSIFICATION_INVOCATIONS / 64;
 
-layout(local_size_x = 64 * tiles_at_once) in;
+layout(local_size_x = CLASSIFICATION_INVOCATIONS) in;
 
-shared uint mirrors[2 * CLASSIFIED_TILES_BY_PIXEL], marks[2 * CLASSIFIED_TILES_BY_PIXEL]; // two words a tile, as tile_masks
+shared uint mirrors[2 * group_tiles], marks[2 * group_tiles]; // two words a tile, as tile_masks
 shared uint surfaces, roughness[ROUGHNESS_BINS];
 
 // Of these pixels of a tile, is it the first of its block?
@@ -39,7 +39,7 @@ bool first_of_block(uvec2 pixels, ivec2 in_tile)
 void main()
 {
     const uint index = gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID;
-    if (index < 2 * CLASSIFIED_TILES_BY_PIXEL)
+    if (index < 2 * group_tiles)
     {
         mirrors[index] = 0;
         marks[index]   = 0;
@@ -48,20 +48,16 @@ void main()
     if (index == 0) surfaces = 0;
     barrier();
 
-    const ivec2 tiles = (size_px + 7) / 8, first_tile = ivec2(gl_WorkGroupID.x * CLASSIFIED_TILES_BY_PIXEL, gl_WorkGroupID.y);
-    const uint  place = index & 63;
-    const ivec2 in_tile = ivec2(place & 7, place >> 3);
-    uint surface_places = 0; // a bit for each tile of this invocation
-    for (uint i = index >> 6; i < CLASSIFIED_TILES_BY_PIXEL; i += tiles_at_once)
+    const ivec2 first_tile = ivec2(gl_WorkGroupID.x * group_tiles, gl_WorkGroupID.y);
+    const uint  own = index >> 6, place = index & 63;
+    const ivec2 in_tile = ivec2(place & 7, place >> 3), pixel = (first_tile + ivec2(own, 0)) * 8 + in_tile;
+    bool inside  = all(lessThan(pixel, size_px));
+    vec4 normal  = inside ? imageLoad(normal_image, pixel) : vec4(0);
+    bool surface = inside && is_surface(load_depth(pixel), normal.xyz);
+    bool mirror  = surface && material_reflects(pixel);
+    SET_BITS(mirrors, own, place, mirror)
+    if (counts_pixels != 0)
     {
-        ivec2 pixel  = (first_tile + ivec2(i, 0)) * 8 + in_tile;
-        bool inside  = all(lessThan(pixel, size_px));
-        vec4 normal  = inside ? imageLoad(normal_image, pixel) : vec4(0);
-        bool surface = inside && is_surface(load_depth(pixel), normal.xyz);
-        bool mirror  = surface && material_reflects(pixel);
-        surface_places |= uint(surface) << i;
-        SET_BITS(mirrors, i, place, mirror)
-        if (counts_pixels == 0) continue;
         uint count = subgroupBallotBitCount(subgroupBallot(surface));
         if (count > 0 && subgroupElect()) atomicAdd(surfaces, count);
         int bin = mirror ? roughness_bin(normal.w) : ROUGHNESS_BINS;
@@ -74,27 +70,23 @@ void main()
         }
     }
     barrier();
-    for (uint i = index >> 6; i < CLASSIFIED_TILES_BY_PIXEL; i += tiles_at_once)
-    {
-        uvec2 reflecting = uvec2(mirrors[2 * i], mirrors[2 * i + 1]);
-        bool  surface    = (surface_places >> i & 1u) != 0;
-        bool  mirror     = (reflecting[in_tile.y >> 2] >> (in_tile.x + 8 * (in_tile.y & 3)) & 1u) != 0;
-        bool  marked     = mirror ? first_of_block(reflecting, in_tile) : every_surface != 0 && surface;
-        SET_BITS(marks, i, place, marked)
-    }
+    uvec2 reflecting = uvec2(mirrors[2 * own], mirrors[2 * own + 1]);
+    bool  marked     = mirror ? first_of_block(reflecting, in_tile) : every_surface != 0 && surface;
+    SET_BITS(marks, own, place, marked)
     barrier();
 
     const ivec2 tile = first_tile + ivec2(index, 0);
-    if (index < CLASSIFIED_TILES_BY_PIXEL && all(lessThan(tile, tiles)))
+    if (index < group_tiles && all(lessThan(tile, size_tiles)))
     {
-        tile_masks[tile.y * tiles.x + tile.x] = uvec2(marks[2 * index], marks[2 * index + 1]);
-        uint reflecting = counts_pixels == 0 ? 0 : bitCount(mirrors[2 * index]) + bitCount(mirrors[2 * index + 1]);
-        if (reflecting > 0)
+        tile_masks[tile.y * size_tiles.x + tile.x] = uvec2(marks[2 * index], marks[2 * index + 1]);
+        uint count = counts_pixels == 0 ? 0 : bitCount(mirrors[2 * index]) + bitCount(mirrors[2 * index + 1]);
+        if (count > 0)
         {
             atomicAdd(reflecting_tiles, 1);
-            atomicAdd(reflecting_pixels, reflecting);
+            atomicAdd(reflecting_pixels, count);
         }
     }
     if (index < ROUGHNESS_BINS && roughness[index] > 0) atomicAdd(roughness_pixels[index], roughness[index]);
     if (index == 0 && surfaces > 0) atomicAdd(surface_pixels, surfaces);
+    if (counts_pixels == 0) list_tiles();
 }

@@ -3,12 +3,14 @@
 #include "rays/reflecting.glsl"
 #include "layout/frame_shared.h"
 
+ivec2 size_tiles = (size_px + 7) / 8;
+
 layout(constant_id = CONSTANT_EVERY_SURFACE) const int every_surface = 0; // trace what does not reflect, too
 layout(constant_id = CONSTANT_TRACE_BLOCK_PX) const int block_px = 1;     // one pixel of each block that reflects
 
-layout(constant_id = CONSTANT_COUNTS_PIXELS) const int counts_pixels = 0; // for the plan; a planned frame only marks
+layout(constant_id = CONSTANT_COUNTS_PIXELS) const int counts_pixels = 0; // for the plan; a planned frame marks and lists
 
-layout(set = 0, binding = 11, scalar) writeonly buffer TileMasks { uvec2 tile_masks[]; }; // bit x + 8 y of a tile, in x and y
+layout(set = 0, binding = 11, scalar) coherent buffer TileMasks { uvec2 tile_masks[]; }; // bit x + 8 y of a tile, in x and y
 layout(set = 0, binding = 6, scalar) buffer PictureStatistics // struct GBufferCounts of trace/counts.h
 {
     uint surface_pixels;
@@ -16,6 +18,8 @@ layout(set = 0, binding = 6, scalar) buffer PictureStatistics // struct GBufferC
     uint reflecting_tiles;
     uint roughness_pixels[ROUGHNESS_BINS];
 };
+
+#include "rays/tile_list.glsl"
 
 // The pixels of a block from its centre outward, row by row where equally far.
 int rank_in_block(ivec2 place)

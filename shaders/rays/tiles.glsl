@@ -1,4 +1,4 @@
-// The tiles of 8 x 8 pixels that shaders/rays/tile_list.comp lists, one for each workgroup of an indirect launch.
+// The tiles of 8 x 8 pixels that shaders/rays/tile_list.glsl lists, one for each workgroup of an indirect launch.
 #include "layout/texels.glsl"
 #include "layout/workgroups.glsl"
 

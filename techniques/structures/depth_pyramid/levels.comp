@@ -1,9 +1,11 @@
-// Up to five levels of the depth pyramid, for GPUs, where dispatches that wait for each other cost more than the work. A workgroup has a square of 16 x 16
-// cells of the first level, an invocation four of them; of each level above a quarter of the invocations before has one.
+// Up to seven levels of the depth pyramid, for GPUs, where dispatches that wait for each other cost more than the work. A workgroup has a square of 64 x 64
+// cells of the first level, an invocation 4 x 4 of them and what lies above; from the fourth level on, a quarter of the invocations before has a cell.
 #include "make_cells.glsl"
 #include "layout/store_cell.glsl"
 
-#define SIDE 8 // of the workgroup
+#define SIDE 16 // of the workgroup
+
+layout(local_size_x = SIDE, local_size_y = SIDE) in;
 
 shared uvec2 made[SIDE * SIDE];
 
@@ -26,12 +28,19 @@ uvec4 stored_pair(ivec2 cell)
 
 void main()
 {
-    ivec2 lane = ivec2(gl_LocalInvocationID.xy), group = ivec2(gl_WorkGroupID.xy), first = 2 * (SIDE * group + lane);
-    uvec4 upper = stored_pair(first), lower = stored_pair(first + ivec2(0, 1));
-    uvec2 made_here = cell_of(false, ivec2(0), upper, lower);
-    for (int above = level + 1; above <= last_level; ++above)
+    ivec2 lane = ivec2(gl_LocalInvocationID.xy), group = ivec2(gl_WorkGroupID.xy);
+    uvec2 quarters[4]; // cells of the second level
+    for (int i = 0; i < 4; ++i)
     {
-        int side = SIDE >> (above - level - 1), place = SIDE * lane.y + lane.x;
+        ivec2 cell  = 2 * (SIDE * group + lane) + ivec2(i & 1, i >> 1);
+        uvec4 upper = stored_pair(2 * cell), lower = stored_pair(2 * cell + ivec2(0, 1));
+        quarters[i] = cell_of(false, ivec2(0), upper, lower);
+        if (level < last_level) store_made(cell, level + 1, quarters[i]);
+    }
+    uvec2 made_here = cell_of(false, ivec2(0), uvec4(quarters[0], quarters[1]), uvec4(quarters[2], quarters[3]));
+    for (int above = level + 2; above <= last_level; ++above)
+    {
+        int side = SIDE >> (above - level - 2), place = SIDE * lane.y + lane.x;
         if (all(lessThan(lane, ivec2(side))))
         {
             store_made(side * group + lane, above, made_here);

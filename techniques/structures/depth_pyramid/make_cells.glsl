@@ -8,7 +8,6 @@
 #include "structure/parameters"
 #include "cell.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant, scalar) uniform Push { int level, last_level; }; // that the dispatch makes
 
 // What a pixel holds in a layer: the bits of its front and of its back; nearest < farthest where there is nothing to hit.
