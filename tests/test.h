@@ -41,11 +41,12 @@ struct PixelPlace {
     size_t i;
     int    x, y;
 };
-inline auto pixels_of(glm::ivec2 size_px)
+inline std::vector<PixelPlace> pixels_of(glm::ivec2 size_px)
 {
-    return std::views::transform(std::views::iota(0, size_px.x * size_px.y), [width = size_px.x](int i) {
-        return PixelPlace{size_t(i), i % width, i / width};
-    });
+    std::vector<PixelPlace> pixels;
+    for (int y = 0; y < size_px.y; ++y)
+        for (int x = 0; x < size_px.x; ++x) pixels.push_back({pixels.size(), x, y});
+    return pixels;
 }
 
 /// Expects of each name that what is found of it is the value that follows it.

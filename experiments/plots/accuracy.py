@@ -7,6 +7,7 @@ from .pairs import Ratio, paired_ratio
 from .paper import height_beside, log_axis, name_lines, sheet, short_names, titled
 from .surfaces import place_of
 
+FEWEST_RUNS = 5  # of a frame, for a curve
 NOT_REACHED = "not reached"
 SUBJECT = "hiz"  # whose speed-ups are the headline; techniques whose names begin with it are its variants, not rivals
 # (prefix of the columns, what they are measured against)

@@ -18,7 +18,8 @@ size_t depth_word(glm::ivec2 size_px, glm::ivec2 pixel)
 size_t plane_place(glm::ivec2 size_px, glm::ivec2 pixel)
 {
     const int first = planes_first(size_px.x, pyramid_rows(pyramid_root(size_px), size_px.y));
-    return static_cast<size_t>(first + strip_index(pixel.x, pixel.y, planes_rows(size_px.y)));
+    const int place = first + strip_index(pixel.x, pixel.y, planes_rows(size_px.y));
+    return static_cast<size_t>(place);
 }
 
 } // namespace

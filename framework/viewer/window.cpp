@@ -106,6 +106,7 @@ void Window::set_picture(const Image& picture)
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
 }
 
+// NOLINTNEXTLINE(performance-no-int-to-ptr): Dear ImGui takes the number of a texture as a pointer
 void* Window::picture() const { return reinterpret_cast<void*>(static_cast<uintptr_t>(texture_)); }
 
 } // namespace ssrlab

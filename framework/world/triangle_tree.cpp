@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <ranges>
 
 namespace ssrlab {
 namespace {
@@ -201,9 +200,9 @@ void refit(TriangleTree& tree, const Scene& moved)
         triangle.c_ws = corner(2);
     }
     // Nodes lie behind their parents.
-    for (TreeNode& node : tree.nodes | std::views::reverse) {
-        fit(tree, node.left_first, node.left_count, node.left_min_ws, node.left_max_ws);
-        fit(tree, node.right_first, node.right_count, node.right_min_ws, node.right_max_ws);
+    for (auto node = tree.nodes.rbegin(); node != tree.nodes.rend(); ++node) {
+        fit(tree, node->left_first, node->left_count, node->left_min_ws, node->left_max_ws);
+        fit(tree, node->right_first, node->right_count, node->right_min_ws, node->right_max_ws);
     }
 }
 

@@ -110,7 +110,7 @@ struct Marcher {
 
     Found interpolated(double t_before, double t, int taken)
     {
-        const Found      sample  = hit(pixel_of(t), march.interval ? t_before : t, t, t, taken);
+        Found            sample  = hit(pixel_of(t), march.interval ? t_before : t, t, t, taken);
         const double     depth   = double(image.depth[pixel_index(sample.pixel, image.view.size_px)]);
         const double     t_front = (depth - ray.origin_px_depth.z) / ray.delta_px_depth.z;
         const glm::ivec2 front   = pixel_of(std::clamp(t_front, t_before, t));

@@ -5,7 +5,6 @@
 #include "frame/world_light.h"
 
 #include <algorithm>
-#include <ranges>
 
 namespace ssrlab {
 namespace {
@@ -201,7 +200,7 @@ void record_followed_light(const Commands& commands, const FrameInputs& frame, c
         shade(onward.lit, &onward != &own.onward.back());
         before = &onward.lit;
     }
-    for (const OnwardRays& onward : own.onward | std::views::reverse) over(onward.sum, onward.lit.list.launch);
+    for (size_t i = own.onward.size(); i-- > 0;) over(own.onward[i].sum, own.onward[i].lit.list.launch);
 }
 
 RecordFunction prepare(Gpu& gpu, const PassContext& context)
