@@ -113,7 +113,7 @@ def law_of_steps(results, tables):
         for axis, axis_ends in zip((top, bottom), ends):
             name_lines(axis, axis_ends)
         if len(flat):
-            message += f"; {listed(flat.series)} {'have' if len(flat) > 1 else 'has'} no such setting"
+            message += "; level lines: tracers without steps"
         titled(figure, message, title)
         yield ("s0_fig11_fig12_" if table is not None else "") + f"fps_steps_{name}", figure
 

@@ -109,7 +109,7 @@ def plain_ticks(axis, values):
     places = sorted(value for value in values if 0 < value < np.inf)
     labelled = places[:1]
     for value in places[1:]:
-        if value >= (places[-1] / places[0]) ** (1 / 11) * labelled[-1]:
+        if value >= (places[-1] / places[0]) ** (1 / 6) * labelled[-1]:
             labelled.append(value)
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_ticks(labelled)

@@ -120,7 +120,7 @@ class Test(Case):
         steps, fps = line_of(left, "OpenGL report")
         self.near([steps, fps], [[25, 50, 100, 250, 500, 1000, 2500], np.array([120, 118, 91, 53, 31, 18, 9]) * 1000 / 7 / 31])
         self.near(line_of(right, "OpenGL report")[1][0], 31 * 7 / 120)
-        self.assertEqual(figure.finding, "From 50 steps on, each step of linear adds 0.01 ms (R² 1.0000); dda has no such setting "
+        self.assertEqual(figure.finding, "From 50 steps on, each step of linear adds 0.01 ms (R² 1.0000); level lines: tracers without steps "
                          "(animal_on_metal, view default, 80×60)")
         self.assertEqual({text.get_text().split(",")[0] for text in left.texts}, {"linear", "dda", "OpenGL report"})
 
