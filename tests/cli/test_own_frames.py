@@ -66,8 +66,9 @@ class Test(Case):
         self.assertTrue(oiio.ImageBufAlgo.channels(frame, kept).write(self.path(name)))
 
     def pixels(self, scene, surface, says=()):
-        printed = self.ssrlab("render", scene, "-t", "hiz", "-p", "max_distance_m=20", "-p", f"surface={surface}", "-o", "p.exr", says=says)
-        return oiio.ImageBuf(self.path("p.exr")).get_pixels(oiio.FLOAT), printed
+        picture = f"{surface}_{scene}"  # OpenImageIO keeps what it has read of a file by that name
+        printed = self.ssrlab("render", scene, "-t", "hiz", "-p", "max_distance_m=20", "-p", f"surface={surface}", "-o", picture, says=says)
+        return oiio.ImageBuf(self.path(picture)).get_pixels(oiio.FLOAT), printed
 
     def test_what_the_surface_model_asks_in_vain_is_said(self):
         self.ssrlab("gbuffer", "builtin:sphere_over_mirror", "--size", "96x54", "-o", "frame.exr")

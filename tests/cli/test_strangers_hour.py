@@ -54,15 +54,15 @@ class Test(Case):
 
     def test_own_frame(self):
         self.follow("tutorials/own_frame.md")
-        for row in self.rows_of("frame", 3):
+        for row in self.rows_of("frame", 5):
             self.assertTrue(row["no_scene_truth"])
             self.assertTrue(row["screen_same_pixel"])
             self.assertTrue(row["picture_rmse"])
 
     def test_own_technique(self):
         self.follow("tutorials/own_technique.md")
-        rows = self.rows_of("mine", 3)
-        self.assertEqual({row["stride_px"] for row in rows if row["technique"] == "strides"}, {"2", "8"})
+        rows = self.rows_of("mine", 5)
+        self.assertEqual({row["stride_px"] for row in rows if row["technique"] == "strides"}, {"1", "2", "4", "8"})
 
     def test_the_tutorial_s_technique_is_the_one_that_new_technique_writes(self):
         trace, = re.findall(r"// mine/strides/trace.glsl\n(.*?)```", read("docs/tutorials/own_technique.md"), re.S)
@@ -70,8 +70,7 @@ class Test(Case):
         self.assertEqual(self.text("mine/strides/trace.glsl").split("\n", 1)[1], trace)
 
     def test_write_a_reprojection(self):
-        printed = self.follow("how-to/write_a_reprojection.md")
-        self.assertIn("to the right, px", printed)
+        self.follow("how-to/write_a_reprojection.md")
         self.assertEqual(len(glob.glob(self.path("orbit_*.png"))), 8)
         self.rows_of("check", 12)
         errors = {row["reprojection"]: (row["reprojection_error_median_px"], row["reprojection_error_p95_px"])
