@@ -316,8 +316,8 @@ TEST_F(LoadFrame, NormalsThatAreZeroComeFromDepthAndShortOnesAreStretched)
         return 3 / (1 + 0.5 * slope);
     };
     whole_frame("depth", z);
-    for (int c = 0; c < 3; ++c)
-        channels_[size_t(1 + c)].second = [=](size_t i) { return i == 10 ? 0 : (i == 20 ? 0.95 : 1) * wall[c]; };
+    for (size_t c = 0; c < 3; ++c)
+        channels_[1 + c].second = [=](size_t i) { return i == 10 ? 0 : (i == 20 ? 0.95 : 1) * wall[int(c)]; };
     const Frame frame = load(std::string(camera) + "[depth]\nkind = 'distance'\n");
     for (const size_t i : {size_t(9), size_t(10), size_t(20)})
         EXPECT_LT(glm::length(glm::dvec3(frame.gbuffer.normal_vs[i]) - wall), 1e-4) << i;
@@ -327,8 +327,8 @@ TEST_F(LoadFrame, NormalsThatAreZeroComeFromDepthAndShortOnesAreStretched)
 TEST_F(LoadFrame, UnsignedNormalsOfZeroWereNeverWrittenAndLongOnesAreNamed)
 {
     whole_frame("depth", [](size_t) { return 0.5; });
-    for (int c = 0; c < 3; ++c) // (0.5, 0.5, 1) stands for +z
-        channels_[size_t(1 + c)].second = [=](size_t i) { return i == 10 ? 0 : c < 2 ? 0.5 : i == 20 ? 2 : 1; };
+    for (size_t c = 0; c < 3; ++c) // (0.5, 0.5, 1) stands for +z
+        channels_[1 + c].second = [=](size_t i) { return i == 10 ? 0 : c < 2 ? 0.5 : i == 20 ? 2 : 1; };
     const Frame frame = load(std::string(camera) + "[depth]\nkind = 'reversed'\n[normals]\nunsigned = true\nspace = "
                                                    "'view'\n");
     EXPECT_LT(glm::length(frame.gbuffer.normal_vs[10] - glm::vec3(0, 0, 1)), 1e-4) << "the depth is that of a wall";

@@ -51,9 +51,10 @@ TEST(TechniqueManifest, AccuracyNamesNumbersAndADirection)
         {"accuracy = { parameter = \"steps\", best = \"lower\" }", ":3: unknown field of 'accuracy' 'best'"},
         {"accuracy = \"steps\"", ":3: 'accuracy' must be"}};
     int number = 0;
-    for (const auto& [line, answer] : mistakes)
-        EXPECT_THAT(message_of<SpecError>([&] { load("mistake" + std::to_string(number++), line); }), HasSubstr(answer))
-            << line;
+    for (const auto& mistake : mistakes) {
+        const auto loaded = [&] { load("mistake" + std::to_string(number++), mistake.first); };
+        EXPECT_THAT(message_of<SpecError>(loaded), HasSubstr(mistake.second)) << mistake.first;
+    }
 }
 
 TEST(TechniqueManifest, WhatAnOwnHitTestIgnoresIsDeclared)
@@ -178,7 +179,8 @@ TEST(TechniqueManifest, MistakesAreNamedWithFileAndLine)
         {"\"two words\" = { default = true, doc = \"d\" }",
          ":4: parameter 'two words' is not a name that GLSL accepts: expected letters, digits"},
         {"float = { default = true, doc = \"d\" }", ":4: parameter 'float' is not a name that GLSL accepts"},
-        {"ray = { default = true, doc = \"d\" }", ":4: parameter 'ray' is not a name that GLSL accepts: it is a name of the shader functions"},
+        {"ray = { default = true, doc = \"d\" }",
+         ":4: parameter 'ray' is not a name that GLSL accepts: it is a name of the shader functions"},
         {"steps = { default = 1, min = 1, max = 2, doc = \"d\" ", ":4: "},
     };
     const TechniqueDir dir;
