@@ -1,6 +1,6 @@
 // What every test has: the frameworks and the parts of the standard library that most use. Precompiled, because parsing
 // these is most of what a test's file costs.
-// Guarded by a macro: a build has failed because g++ 12 took the #pragma once of a precompiled header for no guard.
+// Guarded by a macro: with #pragma once, g++ 12 has read this header again although it was precompiled.
 #ifndef SSRLAB_TESTS_TEST_H
 #define SSRLAB_TESTS_TEST_H
 

@@ -47,6 +47,6 @@ def main(folder, bandwidth_gbps=None):
             table.to_csv(os.path.join(folder, name), index=False, float_format=digits)
     for frame, text in report.write(results, plots, tables):
         print(f"{frame}: {text}")
-    if not plots and len(results.rows):
+    if not plots and len(results.rows) and results.sources.empty:
         print(f"plot: no plot: curves need {accuracy.FEWEST_RUNS} runs of a frame that differ in a setting")
     print(f"{os.path.join(folder, 'report.html')}: {counted(len(plots), 'plot')}, {len(results.rows)} of {counted(len(results.all_rows), 'row')} ok")

@@ -54,7 +54,7 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options)
     Stage stage                    = open_stage(common, catalogue, options);
     const auto [technique, choice] = choose_technique(stage, asked, common.quiet);
     const LabPtr lab               = make_lab(stage, *technique, choice.values, choice.settings.trace);
-    say(common, lacked_channel_text(stage.scene, find_surface(catalogue.surfaces, choice.settings.trace.surface)));
+    say(common, lacked_channel_text(stage.scene, catalogue, choice.settings.trace));
     const TraceImage result = trace_gbuffer(stage.gpu, *make_tracer(stage.gpu, lab));
     write_image(options.output, hits_image(result, technique->id, options.parameters));
     say(common, no_hits_text(*technique, choice.settings.trace, stage.scene, counts_of(result)));

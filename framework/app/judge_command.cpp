@@ -109,7 +109,7 @@ Judged judge_file(const CommonOptions& common, const Catalogue& catalogue, const
     for (const std::string& warning : hits.warnings) say(common, "warning: " + warning);
     Judged              judged{options.frame, options.hits, gbuffer.view.size_px, {}, {}, {}, false, {}};
     const FrameSettings settings = settings_of(catalogue, hits, options.parameters, judged.settings);
-    say(common, lacked_channel_text(frame, find_surface(catalogue.surfaces, settings.trace.surface)));
+    say(common, lacked_channel_text(frame, catalogue, settings.trace));
     judged.judgement = judge_frame(gbuffer, settings.trace, hits);
     if (judged.judgement.rays == 0)
         throw_spec_error("{}: no pixel reflects under these settings, so there is nothing to judge", options.frame);

@@ -99,7 +99,7 @@ int print_plan(const CommonOptions& common, const PlanOptions& options)
     const LabPtr          lab     = make_lab(stage, technique, choice.values, choice.settings.trace);
     const FrameBuffersPtr buffers = make_frame_buffers(stage);
     const FramePlan       plan    = plan_frame(stage, lab, buffers, choice.settings, history);
-    say(common, lacked_channel_text(stage.scene, find_surface(catalogue.surfaces, choice.settings.trace.surface)));
+    say(common, lacked_channel_text(stage.scene, catalogue, choice.settings.trace));
     say(common, no_hits_text(technique, choice.settings.trace, stage.scene, plan.statistics.trace));
     const auto timed = [&](const FramePlan& of) {
         Timed frame{make_frame(stage.gpu, lab, buffers, of, history), {}, {}};

@@ -177,7 +177,7 @@ int explain_ray(const CommonOptions& common, const RayOptions& options)
     Stage                           stage  = open_stage(common, catalogue, options.picture);
     if (exact.size() > 1)
         questions = questions_of(options, catalogue, choose_technique(stage, exact, common.quiet).technique, settings);
-    say(common, lacked_channel_text(stage.scene, find_surface(catalogue.surfaces, settings.trace.surface)));
+    say(common, lacked_channel_text(stage.scene, catalogue, settings.trace));
     if (stage.drawing) draw_layers(stage.gpu, *stage.drawing, settings.trace.layers);
     const Setup      setup{"", read_gbuffer(stage.gpu, *stage.gbuffer), settings.trace, {}};
     const glm::ivec2 pixel  = pixel_option(options.pixel, stage.view.size_px);

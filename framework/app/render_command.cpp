@@ -290,9 +290,7 @@ int render_picture(const CommonOptions& common, const RenderOptions& given)
             const FramePtr         frame =
                 make_frame(stage.gpu, lab, buffers, plan, history, asked.empty() ? Answers::own : Answers::given);
             if (sample == 0) warn_without_reflections(common, plan);
-            if (i == 0 && sample == 0)
-                say(common,
-                    lacked_channel_text(stage.scene, find_surface(catalogue.surfaces, choice.settings.trace.surface)));
+            if (i == 0 && sample == 0) say(common, lacked_channel_text(stage.scene, catalogue, choice.settings.trace));
             if (i == 0 && sample == 0 && !options.truth)
                 say(common, no_hits_text(technique, choice.settings.trace, stage.scene, plan.statistics.trace));
             const bool                first = i == 0 && sample == 0 && !options.truth;

@@ -45,8 +45,9 @@ void say_warnings(const CommonOptions& common, const Scene& scene)
     for (const std::string& warning : scene.warnings) say(common, "warning: " + warning);
 }
 
-std::string lacked_channel_text(const Scene& scene, const Surface& surface)
+std::string lacked_channel_text(const Scene& scene, const Catalogue& catalogue, const TraceSettings& settings)
 {
+    const Surface&    surface = find_surface(catalogue.surfaces, settings.surface);
     const std::string channel = lacked_channel(scene, surface);
     if (channel.empty()) return "";
     return fmt::format("warning: {}: no channel {}: surface = {} takes every surface of this frame as thin", scene.name,

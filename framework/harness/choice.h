@@ -27,7 +27,7 @@ void say(const CommonOptions& common, const std::string& text);
 void say_warnings(const CommonOptions& common, const Scene& scene);
 
 /// Returns what follows where a frame file lacks a channel that the surface model reads; else "".
-std::string lacked_channel_text(const Scene& scene, const Surface& surface);
+std::string lacked_channel_text(const Scene& scene, const Catalogue& catalogue, const TraceSettings& settings);
 
 /// Opens the stage for the frame and device that the options name. Throws SpecError for wrong options.
 Stage open_stage(const CommonOptions& common, const Catalogue& catalogue, const PictureOptions& options);

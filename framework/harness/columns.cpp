@@ -88,7 +88,7 @@ const std::vector<Column> ending = {
      words},
     {"frame_lacks",
      "solid_back: the surface model asks where solids end, and the frame file does not say, so every surface counts as "
-     "thin; empty: nothing lacks",
+     "thin; empty: nothing is missing",
      words},
     {"no_screen_truth", "why the measures that need the screen truth are empty; empty: they have a value", words},
     {"no_scene_truth", "why the measures that need the scene's triangles are empty; empty: they have a value", words},

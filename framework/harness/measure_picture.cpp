@@ -396,10 +396,10 @@ void open_run(SweepContext& sweep, MeasuredPicture& picture, const Run& run, std
     const Technique& technique = find_technique(sweep.techniques, run.technique);
     measured.row               = identity_row(sweep.experiment, run, technique);
     for (const Structure& structure : technique.structures) measured.structures.push_back(structure.id);
-    const Scene&   scene        = sweep.scene->stage.scene;
-    const Surface& surface      = find_surface(sweep.catalogue.surfaces, run.settings.trace.surface);
-    measured.row["frame_lacks"] = lacked_channel(scene, surface);
-    const std::string lacked    = lacked_channel_text(scene, surface);
+    const Scene&         scene    = sweep.scene->stage.scene;
+    const TraceSettings& settings = run.settings.trace;
+    measured.row["frame_lacks"]   = lacked_channel(scene, find_surface(sweep.catalogue.surfaces, settings.surface));
+    const std::string lacked      = lacked_channel_text(scene, sweep.catalogue, settings);
     if (!lacked.empty() && sweep.said.insert(lacked).second) sweep.progress.say(lacked);
     const auto prepare_all = [&] {
         prepare(sweep, picture, measured);
@@ -407,7 +407,7 @@ void open_run(SweepContext& sweep, MeasuredPicture& picture, const Run& run, std
         plan_repeats(sweep, measured);
     };
     if (!try_step(sweep, measured, prepare_all)) return;
-    const std::string no_hits = no_hits_text(technique, run.settings.trace, scene, measured.plan.statistics.trace);
+    const std::string no_hits = no_hits_text(technique, settings, scene, measured.plan.statistics.trace);
     if (!no_hits.empty() && sweep.said.insert(technique.id).second) sweep.progress.say(no_hits);
     sweep.progress.prepared_run(run.id, cost_of(sweep, run));
     open.push_back(std::move(measured));

@@ -42,7 +42,7 @@ struct SweepContext {
     std::map<std::string, SequenceState> sequences =
         {}; // of one scene, view and size, by sequence_id(); empty for a single frame
     std::vector<ConvergedPicture> converged = {}; // likewise; empty if more than the jitter moves
-    std::set<std::string>         said      = {}; // techniques without hits and channels that lack, said once
+    std::set<std::string>         said      = {}; // techniques without hits and missing channels, each said once
     // Wall time of timing, of counting and judging, and of making or reading truths.
     double timed_s = 0, counted_s = 0, truths_s = 0;
 };
